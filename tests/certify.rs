@@ -160,13 +160,13 @@ fn tables_beyond_the_memory_do_not_cost_the_placement() {
 #[test]
 fn memory_used_up_on_the_way_leaves_the_bound_reached() {
     let bench = bench();
-    bench.replace(RUN, "[constraints]", "[certificate]\ngap_percent = 0.001\nmemory_gb = 0.0025\n[constraints]");
+    bench.replace(RUN, "[constraints]", "[certificate]\ngap_percent = 0.001\nmemory_gb = 0.0050\n[constraints]");
     let ended = place(&bench, &["--threads", "2"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    ended.assert_says(&["the 0.00250 GB of certificate.memory_gb are used up: "]);
+    ended.assert_says(&["the 0.00500 GB of certificate.memory_gb are used up: "]);
     let found = certificate(&bench);
     assert_eq!(found["best"]["status"], "memory", "{found:#}");
-    assert!(found["best_reason"].as_str().unwrap().starts_with("the 0.00250 GB of certificate.memory_gb"));
+    assert!(found["best_reason"].as_str().unwrap().starts_with("the 0.00500 GB of certificate.memory_gb"));
     // It is counted, not measured.
     assert_eq!(place(&bench, &["--threads", "1"]).code, Some(0));
     assert_eq!(certificate(&bench), found);

@@ -29,7 +29,9 @@ pub(super) fn bound_of(leaf: &Leaf, value: f64, settings: &CertificateSettings, 
 
 /// The same of an upright tool.
 fn upright(problem: &Problem, value: f64, settings: &CertificateSettings, monitor: &Monitor) -> Bound {
-    let (CertificateSettings { gap, memory, .. }, start) = (*settings, Instant::now());
+    let CertificateSettings { gap, memory, .. } = *settings;
+    let (spent, threads) = (Spent::default(), rayon::current_num_threads() as u64);
+    let since = Instant::now();
     let (model, whole) = (Model::new(problem), whole(problem));
     let Model { keeps, objective, .. } = model;
     let search = BranchAndBound { sense: Sense::Min, value, gap, keeps, objective, memory };
@@ -44,21 +46,23 @@ fn upright(problem: &Problem, value: f64, settings: &CertificateSettings, monito
         Ok(begun) => begun,
         Err(stop) => return search.not_begun(whole, stop),
     };
+    spent.add(TABLES, threads, since);
     let full = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
     // Parts of finer tables are for many boxes each: for a few the cells of heading take less time.
+    let since = Instant::now();
     let at_once = left.len() < MANY || with_cells_at_once(&model, &coarse, &left, ceiling, monitor);
-    let spent = Spent::default();
-    // All threads made the tables.
-    (0..rayon::current_num_threads()).for_each(|_| spent.add(false, start));
+    spent.add(CELLS, threads, since);
     let known = at_once.then(|| Arc::clone(&full));
     let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: known.clone() }).collect();
     let all = Parts {
         start,
         nodes,
         of: |open: &Open<Known>| {
-            let begun = Instant::now();
+            let since = Instant::now();
             let parts = parts(&model, &coarse, open, ceiling, monitor);
-            spent.add(open.known.is_some(), begun);
+            // A box of which no cells were known may be bounded by them now.
+            let is_by_cells = parts.iter().flatten().any(|part| part.known.is_some());
+            spent.add(if is_by_cells { CELLS } else { TABLES }, 1, since);
             parts
         },
         used: || model.used() + coarse.used(),
@@ -85,13 +89,19 @@ fn sums(model: &Model, region: &Region, active: &ActiveCells, value: f64) -> Opt
     sums.iter().all(|sum| sum.is_finite()).then_some(sums)
 }
 
-/// The time of all threads: that of coarse tables with their finer levels, and that of cells of heading.
+/// The time of all threads, by what it went into.
 #[derive(Default)]
 struct Spent([AtomicU64; 2]);
 
+/// Coarse tables with their finer levels.
+const TABLES: usize = 0;
+/// Cells of heading.
+const CELLS: usize = 1;
+
 impl Spent {
-    fn add(&self, is_cells: bool, begun: Instant) {
-        self.0[usize::from(is_cells)].fetch_add(begun.elapsed().as_nanos() as u64, Ordering::Relaxed);
+    /// Adds the time of so many threads.
+    fn add(&self, part: usize, threads: u64, since: Instant) {
+        self.0[part].fetch_add(threads * since.elapsed().as_nanos() as u64, Ordering::Relaxed);
     }
 
     /// s

@@ -7,7 +7,7 @@
 
 use super::arm::{Arm, ArmCompliance};
 use super::cell::Extent;
-use super::enclosure::{Enclosure, FUNCTIONS, Interval, REMAINDERS, Remainder, ValueRange, bends, digits, left_out};
+use super::enclosure::{Enclosure, FUNCTIONS, Interval, REMAINDERS, Remainder, ValueRange, bends, digits};
 use super::interval_simd::{Lanes, WIDTH};
 use super::moment::{MOMENTS, MomentModel};
 use super::region::PolarModel;
@@ -297,8 +297,8 @@ pub(super) fn known_over(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], c
     }
 }
 
-/// In which of four regions (radius, height, heading) no state is allowed, as far as intervals for values alone tell: in
-/// a tenth of the time, of most of those that are empty.
+/// In which of four regions (radius, height, heading) no state is allowed, as far as intervals for values alone tell:
+/// of most of those that are empty, without their derivatives.
 fn are_empty(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], class: PostureClass) -> [bool; WIDTH] {
     let (sine, cosine) = ValueRange::turning(place.map(|p| p[2]), half[2]);
     let side =
@@ -336,8 +336,7 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
         [f.value.0[lane], f.gradient[0].0[lane], f.gradient[1].0[lane], f.gradient[2].0[lane]]
     };
     let values = functions.map(of);
-    let (digits, most) = (digits(&functions, lane, half), left_out(&functions, lane, half));
-    let Some(remainder) = Remainder::new(bends(&functions, lane), digits, most) else {
+    let Some(remainder) = Remainder::new(bends(&functions, lane), digits(&functions, lane, half)) else {
         return (Node::Unknown, None);
     };
     let known = Node::Known(AffineModel { values: values.map(|v| v.map(|x| x as f32)), remainder, sure });

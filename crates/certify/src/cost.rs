@@ -17,8 +17,8 @@ pub(super) type Known<'a> = (&'a AffineModel, Option<&'a MomentModel>);
 /// The corners of a box.
 pub(super) const CORNERS: usize = 8;
 
-/// What of its uncertainty a bound leaves out: as it is, to see what that takes away, without what models leave out, and
-/// without the width of cells of heading too. Only the first is a bound.
+/// What of its uncertainty a bound does not count, to see what that takes away: nothing of it, what models leave out,
+/// or the width of cells of heading too. Only the first gives a bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Without {
     Nothing,

@@ -181,12 +181,11 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
         Self { value: Interval::point(middle.value), gradient: [zero; V], second: [zero; P], middle, half }
     }
 
-    /// Cuts each interval down to what the middle and the next derivatives leave of it.
-    // In place: it is large to copy.
-    #[inline(never)]
-    fn tighten(&mut self) {
+    /// With each interval cut down to what the middle and the next derivatives leave of it, where there are any.
+    #[inline]
+    fn tightened(mut self) -> Self {
         if V == 0 {
-            return;
+            return self;
         }
         let h = self.half;
         let max_second = self.second.map(Interval::magnitude);
@@ -206,12 +205,13 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
             radius = radius + max_second[p] * (if i == j { 0.5 } else { 1.0 } * h[*i] * h[*j]);
         }
         self.value = self.value.cut(Interval { middle: self.middle.value, radius });
+        self
     }
 
     /// A function of it, from intervals that hold its value and first two derivatives, and these in the middle.
     #[inline(never)]
     fn through(self, middle: Slope<V>, value: Interval, first: Interval, second: Interval) -> Self {
-        let mut out = Self {
+        Self {
             value,
             gradient: self.gradient.map(|g| g.mul(first)),
             second: std::array::from_fn(|p| {
@@ -221,9 +221,8 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
             }),
             middle,
             half: self.half,
-        };
-        out.tighten();
-        out
+        }
+        .tightened()
     }
 }
 
@@ -251,17 +250,13 @@ pub(super) struct Remainder<const N: usize> {
     bends: [[f32; N]; PAIRS],
     /// What is lost by writing the model with fewer digits.
     digits: [f32; N],
-    /// What is left out in all of the region at most: of two functions together that is less than what the pairs of
-    /// variables make of both.
-    most: [f32; N],
 }
 
 impl<const N: usize> Remainder<N> {
-    /// Rounded up; `None` where it is not finite. `most` is what is left out in all of the region, but for digits.
-    pub fn new(bends: [[f64; N]; PAIRS], digits: [f64; N], most: [f64; N]) -> Option<Self> {
+    /// Rounded up; `None` where it is not finite.
+    pub fn new(bends: [[f64; N]; PAIRS], digits: [f64; N]) -> Option<Self> {
         let up = |x: f64| (x * (1.0 + 1e-6)) as f32;
-        let most = std::array::from_fn(|f| up(most[f] + digits[f]));
-        let made = Self { bends: bends.map(|of| of.map(up)), digits: digits.map(up), most };
+        let made = Self { bends: bends.map(|of| of.map(up)), digits: digits.map(up) };
         let is_fine = |x: &f32| *x < 1e30;
         (made.digits.iter().all(is_fine) && made.bends.iter().flatten().all(is_fine)).then_some(made)
     }
@@ -274,7 +269,6 @@ impl<const N: usize> Remainder<N> {
         for (bends, factor) in self.bends.iter().zip(<Enclosure>::pair_factors(h)) {
             (0..N).for_each(|f| out[f] += factor * f64::from(bends[f]));
         }
-        (0..N).for_each(|f| out[f] = out[f].min(f64::from(self.most[f])));
         out
     }
 
@@ -290,14 +284,8 @@ impl<const N: usize> Remainder<N> {
     #[cfg(test)]
     pub fn times(self, factors: [f32; N]) -> Self {
         let times = |of: [f32; N]| std::array::from_fn(|f| factors[f] * of[f]);
-        Self { bends: self.bends.map(times), digits: times(self.digits), most: times(self.most) }
+        Self { bends: self.bends.map(times), digits: times(self.digits) }
     }
-}
-
-/// Of functions one by one: that of m, the length of those of d1 and d2, that of those of c_rz and c_tz, and that of
-/// c_zz.
-fn grouped(of: impl Fn(usize) -> f64) -> [f64; REMAINDERS] {
-    [of(0), libm::hypot(of(1), of(2)), libm::hypot(of(3), of(4)), of(5)]
 }
 
 /// The largest second derivatives of functions by pair of variables: of m, of the length of (d1, d2), of that of (c_rz,
@@ -306,17 +294,10 @@ pub(super) fn bends<const V: usize, const P: usize>(
     functions: &[&Enclosure<V, P>; FUNCTIONS],
     lane: usize,
 ) -> [[f64; REMAINDERS]; P] {
-    std::array::from_fn(|p| grouped(|f| functions[f].second[p].magnitude().0[lane]))
-}
-
-/// What affine models of the same leave out in all of the region.
-pub(super) fn left_out<const V: usize, const P: usize>(
-    functions: &[&Enclosure<V, P>; FUNCTIONS],
-    lane: usize,
-    half: [f64; V],
-) -> [f64; REMAINDERS] {
-    let factors = Enclosure::<V, P>::pair_factors(half);
-    grouped(|f| (0..P).map(|p| functions[f].second[p].magnitude().0[lane] * factors[p]).sum())
+    std::array::from_fn(|p| {
+        let of = |f: usize| functions[f].second[p].magnitude().0[lane];
+        [of(0), libm::hypot(of(1), of(2)), libm::hypot(of(3), of(4)), of(5)]
+    })
 }
 
 /// What is lost of the same by writing values and gradients with fewer digits.

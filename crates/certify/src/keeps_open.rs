@@ -105,8 +105,8 @@ impl KeepsOpen {
 }
 
 impl fmt::Display for KeepsOpen {
-    /// `of the states that still count 3 % are unknown and 61 % undecided (conditioning 60 %, joint 3 2 %); their points
-    /// come to 0.85 of the value, 1.01 without remainders, 1.02 without the heading's part too; 45 s of two ..`.
+    /// `of the states that still count 3 % are unknown and 61 % undecided (conditioning 60 %, joint 3 2 %); in these
+    /// boxes the points come to 0.852 of the value, ..; 58 s of all threads went into coarse tables, ..`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [unknown, undecided] = [self.unknown, self.undecided].map(|count| self.percent(count));
         write!(f, "of the states that still count {unknown} % are unknown and {undecided} % undecided")?;

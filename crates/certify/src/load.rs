@@ -206,7 +206,7 @@ impl Load {
             let direction = self.directions[0];
             let response = at.times(direction);
             let sign = if dot(direction, moved) < 0.0 { -1.0 } else { 1.0 };
-            let sharp = scaled(response, self.error * NO_LONGER / norm(response).max(f64::MIN_POSITIVE));
+            let sharp = self.error_along(response);
             // The mean of that with u and that with -u: a moment adds nothing to it.
             let of_error = Tangent { along: [0.0; 3], ..Tangent::new(direction, sharp) };
             return (Tangent::new(direction.map(|x| sign * x), self.force).plus(&of_error), Some(of_error));
@@ -220,8 +220,7 @@ impl Load {
         let response = at.times(self.parts_back(moved));
         let sign = if dot(response, aside) < 0.0 { -norm(response) } else { norm(response) };
         let under = |error: [f64; 3]| {
-            let step = self.error * NO_LONGER / norm(error).max(f64::MIN_POSITIVE);
-            let force = std::array::from_fn(|k| self.force[k] + step * error[k]);
+            let force = added(self.force, self.error_along(error));
             (force, added(at.times(force), by_moment))
         };
         let (mut force, mut moved) = under(std::array::from_fn(|k| response[k] + sign * aside[k]));
@@ -231,14 +230,18 @@ impl Load {
         (Tangent::new(self.along(moved), force), None)
     }
 
-    /// A tangent that is nearly sharp there, in a fraction of the time: u along the deflection without an error, and the
-    /// error that adds most to that.
+    /// A tangent that is nearly sharp there, in a fraction of the time: u along the deflection without an error, and
+    /// the error that adds most to that.
     #[inline(always)]
     pub fn near_tangent(&self, at: &Yielding, by_moment: [f64; 3]) -> Tangent {
         let along = self.along(added(at.times(self.force), by_moment));
-        let response = at.times(along);
-        let error = scaled(response, self.error * NO_LONGER / norm(response).max(f64::MIN_POSITIVE));
-        Tangent::new(along, added(self.force, error))
+        Tangent::new(along, added(self.force, self.error_along(at.times(along))))
+    }
+
+    /// The largest error of the force in a direction.
+    #[inline(always)]
+    fn error_along(&self, direction: [f64; 3]) -> [f64; 3] {
+        scaled(direction, self.error * NO_LONGER / norm(direction).max(f64::MIN_POSITIVE))
     }
 
     /// W^T W times a deflection.

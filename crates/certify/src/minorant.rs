@@ -258,7 +258,7 @@ pub(super) struct OfKind<'a> {
     least: Vec<(f64, [f64; 3])>,
 }
 
-/// Regions looked at once more by sharp tangents, at most.
+/// Regions evaluated again with sharp tangents, at most.
 const SHARPENED: usize = 8;
 
 impl<'a> OfKind<'a> {
@@ -278,7 +278,8 @@ impl<'a> OfKind<'a> {
         let (turned, of_part) = (direction.factors(&first), load.of_part(&first));
         let score = |region: &ModelledRegion, is_sharp| region.least_score(load, direction, h_chi, is_sharp);
         let sharp = |region: &ModelledRegion| score(region, true);
-        let is_above_zero = if !load.is_single() {
+        // Without errors of the force the one is as sharp as the other.
+        let is_above_zero = if !load.is_single() && load.error > 0.0 {
             let is_above_zero = self.each(|region| score(region, false), sharp);
             if is_above_zero {
                 self.sharpen(h_chi, sharp);

@@ -4,8 +4,8 @@
 //! `<D, W^T u m^T>`. D is not symmetric: in the plan it has a mean P, an antisymmetric part A and a pair that turns
 //! twice as fast as the frame; its columns and rows along axis 1 are two pairs that turn with the frame.
 
-use super::enclosure::{Enclosure, Remainder};
-use super::number::{PAIRS, VARIABLES};
+use super::enclosure::Remainder;
+use super::number::VARIABLES;
 
 /// Functions modelled: P, A, (D_rr - D_tt) / 2, (D_rt + D_tr) / 2, D_rz, D_tz, D_zr, D_zt and D_zz.
 pub(super) const MOMENTS: usize = 9;
@@ -26,15 +26,12 @@ impl MomentModel {
     /// Of values and gradients at a node, and second derivatives by pairs of variables (function, pair); `None` where
     /// they are not finite.
     pub fn new(values: [[f64; 4]; MOMENTS], half: [f64; 3], of_pair: impl Fn(usize, usize) -> f64) -> Option<Self> {
-        let grouped = |of: &dyn Fn(usize) -> f64| {
-            GROUPS.map(|(first, count, _)| (first..first + count).map(|f| of(f).powi(2)).sum::<f64>().sqrt())
-        };
-        let bends = std::array::from_fn(|pair| grouped(&|f| of_pair(f, pair)));
-        let factors = <Enclosure>::pair_factors(half);
-        let most = grouped(&|f| (0..PAIRS).map(|pair| of_pair(f, pair) * factors[pair]).sum());
+        let bends = std::array::from_fn(|pair| {
+            GROUPS.map(|(first, count, _)| (first..first + count).map(|f| of_pair(f, pair).powi(2)).sum::<f64>().sqrt())
+        });
         let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();
         let digits = GROUPS.map(|(first, count, _)| 1e-7 * (first..first + count).map(size).sum::<f64>());
-        let remainder = Remainder::new(bends, digits, most)?;
+        let remainder = Remainder::new(bends, digits)?;
         Some(Self { values: values.map(|v| v.map(|x| x as f32)), remainder })
     }
 }

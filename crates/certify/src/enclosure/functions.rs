@@ -134,15 +134,14 @@ impl<const V: usize, const P: usize> Add for Enclosure<V, P> {
     type Output = Self;
     #[inline(never)]
     fn add(self, other: Self) -> Self {
-        let mut out = Self {
+        Self {
             value: self.value.add(other.value),
             gradient: std::array::from_fn(|k| self.gradient[k].add(other.gradient[k])),
             second: std::array::from_fn(|p| self.second[p].add(other.second[p])),
             middle: self.middle + other.middle,
             half: widths(&self, &other),
-        };
-        out.tighten();
-        out
+        }
+        .tightened()
     }
 }
 
@@ -150,15 +149,14 @@ impl<const V: usize, const P: usize> Sub for Enclosure<V, P> {
     type Output = Self;
     #[inline(never)]
     fn sub(self, other: Self) -> Self {
-        let mut out = Self {
+        Self {
             value: self.value.sub(other.value),
             gradient: std::array::from_fn(|k| self.gradient[k].sub(other.gradient[k])),
             second: std::array::from_fn(|p| self.second[p].sub(other.second[p])),
             middle: self.middle - other.middle,
             half: widths(&self, &other),
-        };
-        out.tighten();
-        out
+        }
+        .tightened()
     }
 }
 
@@ -167,7 +165,7 @@ impl<const V: usize, const P: usize> Mul for Enclosure<V, P> {
     #[inline(never)]
     fn mul(self, other: Self) -> Self {
         let (a, b) = (&self, &other);
-        let mut out = Self {
+        Self {
             value: a.value.mul(b.value),
             gradient: std::array::from_fn(|k| a.gradient[k].mul(b.value).add(b.gradient[k].mul(a.value))),
             second: std::array::from_fn(|p| {
@@ -179,9 +177,8 @@ impl<const V: usize, const P: usize> Mul for Enclosure<V, P> {
             }),
             middle: self.middle * other.middle,
             half: widths(a, b),
-        };
-        out.tighten();
-        out
+        }
+        .tightened()
     }
 }
 
@@ -215,7 +212,7 @@ impl<const V: usize, const P: usize> Number for Enclosure<V, P> {
     }
     #[inline(never)]
     fn square(self) -> Self {
-        let mut out = Self {
+        Self {
             value: self.value.square(),
             gradient: self.gradient.map(|g| g.mul(self.value).scale(2.0)),
             second: std::array::from_fn(|p| {
@@ -225,9 +222,8 @@ impl<const V: usize, const P: usize> Number for Enclosure<V, P> {
             }),
             middle: self.middle.square(),
             half: self.half,
-        };
-        out.tighten();
-        out
+        }
+        .tightened()
     }
     #[inline(never)]
     fn sqrt(self) -> Self {

@@ -2,7 +2,7 @@
 //! spindle about its axis.
 
 use super::super::arm::{Arm, ArmCompliance};
-use super::super::enclosure::{Enclosure, FUNCTIONS, REMAINDERS, digits, left_out};
+use super::super::enclosure::{Enclosure, FUNCTIONS, REMAINDERS, bends, digits};
 use super::super::interval_simd::{Lanes, WIDTH};
 use super::super::keeps_open::KeepsOpen;
 use super::super::kind::Kind;
@@ -88,8 +88,10 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosed>, lane: usize, half: [f64; LEANI
         return Known::Unknown;
     }
     let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1], &y.axial];
-    let (digits, left_out) = (digits(&functions, lane, half), left_out(&functions, lane, half));
-    let remainder: [f64; REMAINDERS] = std::array::from_fn(|f| digits[f] + left_out[f]);
+    let mut remainder = digits(&functions, lane, half);
+    for (bends, factor) in bends(&functions, lane).into_iter().zip(Enclosed::pair_factors(half)) {
+        (0..REMAINDERS).for_each(|f| remainder[f] += factor * bends[f]);
+    }
     if !remainder.iter().all(|r| *r < 1e30) {
         return Known::Unknown;
     }
