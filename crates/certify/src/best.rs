@@ -15,24 +15,23 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use stead_numerics::monitor::{Monitor, Stop};
-use stead_problem::problem::Problem;
 use stead_problem::sense::Sense;
 use stead_problem::settings::CertificateSettings;
 
 /// Bounds the objective of all placements from below: see [`super::best()`].
 pub(super) fn bound_of(leaf: &Leaf, value: f64, settings: &CertificateSettings, monitor: &Monitor) -> Bound {
     match leaf.leans {
-        true => leaning::best(&leaf.problem, value, settings, monitor),
-        false => upright(&leaf.problem, value, settings, monitor),
+        true => leaning::best(&leaf.problem, &leaf.pieces, value, settings, monitor),
+        false => upright(leaf, value, settings, monitor),
     }
 }
 
 /// The same of an upright tool.
-fn upright(problem: &Problem, value: f64, settings: &CertificateSettings, monitor: &Monitor) -> Bound {
+fn upright(leaf: &Leaf, value: f64, settings: &CertificateSettings, monitor: &Monitor) -> Bound {
     let CertificateSettings { gap, memory, .. } = *settings;
     let (spent, threads) = (Spent::default(), rayon::current_num_threads() as u64);
     let since = Instant::now();
-    let (model, whole) = (Model::new(problem), whole(problem));
+    let (model, whole) = (Model::of(&leaf.problem, &leaf.pieces), whole(&leaf.problem));
     let Model { keeps, objective, .. } = model;
     let search = BranchAndBound { sense: Sense::Min, value, gap, keeps, objective, memory };
     // Of no placement anything is known until the tables are made.
@@ -68,15 +67,21 @@ fn upright(problem: &Problem, value: f64, settings: &CertificateSettings, monito
         used: || model.used() + coarse.used(),
         bytes: |active: &Known| active.as_ref().map_or(0, |active| active.bytes()),
         count: |counted: &mut KeepsOpen, region: &Region, known: &Known| {
-            let active = known.as_deref().unwrap_or(&full);
-            some_points(model.points.len()).for_each(|point| counted.add_point(&model, region, active, point));
-            let open = Open { bound: 0.0, region: *region, known: None };
-            let own = known.clone().or_else(|| with_cells(&model, &open, f64::INFINITY, &Monitor::silent()).known);
-            counted.add_sums(own.and_then(|active| sums(&model, region, &active, value)));
+            count_box(&model, counted, region, known, value);
             counted.seconds = Some(spent.seconds());
         },
     };
     search.explore(all, monitor, |_| None)
+}
+
+/// Counts what is known of the states of a box, and what takes its bound down.
+pub(super) fn count_box(model: &Model, counted: &mut KeepsOpen, region: &Region, known: &Known, value: f64) {
+    let full = || Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
+    let active = known.clone().unwrap_or_else(full);
+    some_points(model.points.len()).for_each(|point| counted.add_point(model, region, &active, point));
+    let open = Open { bound: 0.0, region: *region, known: None };
+    let own = known.clone().or_else(|| with_cells(model, &open, f64::INFINITY, &Monitor::silent()).known);
+    counted.add_sums(own.and_then(|active| sums(model, region, &active, value)));
 }
 
 /// What the points come to at least in a box, in terms of the value: as its bound has it, without what models leave
@@ -91,21 +96,21 @@ fn sums(model: &Model, region: &Region, active: &ActiveCells, value: f64) -> Opt
 
 /// The time of all threads, by what it went into.
 #[derive(Default)]
-struct Spent([AtomicU64; 2]);
+pub(super) struct Spent([AtomicU64; 2]);
 
 /// Coarse tables with their finer levels.
-const TABLES: usize = 0;
+pub(super) const TABLES: usize = 0;
 /// Cells of heading.
-const CELLS: usize = 1;
+pub(super) const CELLS: usize = 1;
 
 impl Spent {
     /// Adds the time of so many threads.
-    fn add(&self, part: usize, threads: u64, since: Instant) {
+    pub fn add(&self, part: usize, threads: u64, since: Instant) {
         self.0[part].fetch_add(threads * since.elapsed().as_nanos() as u64, Ordering::Relaxed);
     }
 
     /// s
-    fn seconds(&self) -> [f64; 2] {
+    pub fn seconds(&self) -> [f64; 2] {
         self.0.each_ref().map(|nanoseconds| nanoseconds.load(Ordering::Relaxed) as f64 * 1e-9)
     }
 }
@@ -186,13 +191,13 @@ const WORTH: usize = 4;
 const AFFORDABLE: usize = 600_000;
 
 /// The cells of heading that are still of interest in a box, once they are used.
-type Known = Option<Arc<ActiveCells>>;
+pub(super) type Known = Option<Arc<ActiveCells>>;
 
 /// The halves of a box with their bounds; `None` where it is not to be cut further.
 ///
 /// As long as the coarse tables have a level for the halves their bound is by these alone, which takes a thousandth of
 /// the time. Then come the cells of heading, and with them the limits on beta.
-fn parts(
+pub(super) fn parts(
     model: &Model,
     coarse: &CoarseBounds,
     open: &Open<Known>,

@@ -39,6 +39,17 @@ pub struct Bound {
     pub open: Vec<(Region, f64)>,
 }
 
+/// The open boxes of a part of a problem that is bounded by itself: of one orientation of the part, and of one segment.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct OpenIn {
+    /// The name of the orientation, where there are several.
+    pub orientation: Option<String>,
+    /// The number of the segment, from 1, where segments are bounded one by one.
+    pub segment: Option<usize>,
+    /// How many boxes are open in it.
+    pub boxes: usize,
+}
+
 /// How a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -75,7 +86,7 @@ impl Bound {
 }
 
 /// Boxes taken at once; the result depends on it, so it is fixed.
-const BATCH: usize = 64;
+pub(super) const BATCH: usize = 64;
 /// Half widths of the boxes that tables are first requested in detail: radius and height (m), yaw (rad).
 const START: [f64; 3] = [0.009, 0.0125, 0.0157];
 /// Boxes whose half widths are this much smaller are not cut further.
@@ -213,6 +224,16 @@ impl BranchAndBound {
         Bound { value: self.value, met, bound, with_rate, with_turn, nodes, status, keeps_open: None, open }
     }
 
+    /// The bound where the points together do not get past `sum`.
+    fn rounded(&self, sum: f64) -> f64 {
+        self.objective.value(sum) * (1.0 + self.sign() * ROUNDING)
+    }
+
+    /// What a search from below that ended like this has found: the points come to `sum` at least.
+    pub fn ended(&self, sum: f64, nodes: usize, status: Status, open: Vec<(Region, f64)>) -> Bound {
+        self.found(None, self.rounded(sum.min(self.ceiling())), nodes, status, open)
+    }
+
     /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, the memory is used up, or
     /// the bound can no longer change.
     ///
@@ -254,7 +275,7 @@ impl BranchAndBound {
         let sign = self.sign();
         let left = queue.left();
         let farthest = left.iter().map(|queued| queued.rank).fold(sign * self.ceiling(), f64::max);
-        let bound = self.objective.value(sign * farthest) * (1.0 + sign * ROUNDING);
+        let bound = self.rounded(sign * farthest);
         let value = |queued: &Queued<T>| self.objective.value(queued.open.bound);
         let open = left.iter().map(|queued| (queued.open.region, value(queued))).collect();
         let mut found = self.found(met, bound, nodes, status, open);

@@ -104,34 +104,62 @@ pub(super) fn too_near(problem: &Problem) -> Option<f64> {
 /// Nearer to axis 1 nothing is known of a path point. m
 pub(super) const NEAREST: f64 = 0.05;
 
-/// Which yaws less azimuth the cell allows.
+/// Which radii and yaws less azimuth a cell allows, or the pieces that it is made of.
+#[derive(Debug, Clone)]
+pub(super) struct Yaws(pub(super) Vec<CellPiece>);
+
+/// One of them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Yaws {
-    /// Middle and half width of the range, where it is not the whole turn. rad
-    pub(super) range: Option<(f64, f64)>,
+pub(super) struct CellPiece {
+    /// From and to. m
+    radius: [f64; 2],
+    /// Middle and half width of the range of yaw less azimuth, where it is not the whole turn. rad
+    pub range: Option<(f64, f64)>,
 }
 
+/// What a piece is larger than computed by. m, rad
+const LARGER: f64 = 1e-9;
+
 impl Yaws {
+    /// Of the cell of a problem.
     pub fn new(problem: &Problem) -> Self {
-        let cell = &problem.cell;
-        let [[x0, x1], [y0, y1]] = corners(cell, problem);
-        let around = x0 <= 0.0 && x1 >= 0.0 && y0 <= 0.0 && y1 >= 0.0;
-        if cell.is_yaw_free() || around {
-            return Self { range: None };
-        }
-        // Azimuths of the four corners about that of the middle: less than half a turn apart in all.
-        let middle = libm::atan2(y0 + y1, x0 + x1);
-        let off = |x: f64, y: f64| wrap(libm::atan2(y, x) - middle);
-        let all = [off(x0, y0), off(x0, y1), off(x1, y0), off(x1, y1)];
-        let (low, high) =
-            (all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max));
-        let (from, to) = (cell.yaw.min - middle - high, cell.yaw.max - middle - low);
-        let range = (to - from < TAU).then_some((side(problem) * (from + to) / 2.0, (to - from) / 2.0 + 1e-9));
-        Self { range }
+        Self::of(&[problem.cell], problem)
     }
 
-    /// Whether some placement of a box is in the cell, as far as its yaw tells.
-    pub fn allow(&self, region: &Region) -> bool {
-        self.range.is_none_or(|(middle, half)| wrap(region.middle[2] - middle).abs() <= half + region.half[2])
+    /// Of several cells, of which a placement is in any.
+    pub fn of(cells: &[Cell], problem: &Problem) -> Self {
+        let one = |cell: &Cell| {
+            let Region { middle, half } = whole(&problem.in_cell(*cell));
+            let radius = [middle[0] - half[0] - LARGER, middle[0] + half[0] + LARGER];
+            CellPiece { radius, range: range(cell, problem) }
+        };
+        Self(cells.iter().map(one).collect())
     }
+
+    /// Whether some placement of a box is in the cell, as far as its radius and yaw tell.
+    pub fn allow(&self, region: &Region) -> bool {
+        let ([radius, _, turn], [half, _, half_turn]) = (region.middle, region.half);
+        self.0.iter().any(|piece| {
+            let [near, far] = piece.radius;
+            let is_near = radius - half <= far && radius + half >= near;
+            is_near && piece.range.is_none_or(|(middle, half)| wrap(turn - middle).abs() <= half + half_turn)
+        })
+    }
+}
+
+/// Middle and half width of the range of yaw less azimuth of a cell, where it is not the whole turn. rad
+fn range(cell: &Cell, problem: &Problem) -> Option<(f64, f64)> {
+    let [[x0, x1], [y0, y1]] = corners(cell, problem);
+    let around = x0 <= 0.0 && x1 >= 0.0 && y0 <= 0.0 && y1 >= 0.0;
+    if cell.is_yaw_free() || around {
+        return None;
+    }
+    // Azimuths of the four corners about that of the middle: less than half a turn apart in all.
+    let middle = libm::atan2(y0 + y1, x0 + x1);
+    let off = |x: f64, y: f64| wrap(libm::atan2(y, x) - middle);
+    let all = [off(x0, y0), off(x0, y1), off(x1, y0), off(x1, y1)];
+    let (low, high) =
+        (all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+    let (from, to) = (cell.yaw.min - middle - high, cell.yaw.max - middle - low);
+    (to - from < TAU).then_some((side(problem) * (from + to) / 2.0, (to - from) / 2.0 + LARGER))
 }

@@ -1,8 +1,8 @@
 //! The certificate: bounds around the best and the worst placement found, what they relax, and how they ended.
 
-use super::branch_and_bound::{Bound, Status};
+use super::branch_and_bound::{Bound, OpenIn, Status};
 use super::cell::NEAREST;
-use super::part::{OpenIn, Part, are_segments_apart, expected_cost, together};
+use super::part::{Part, expected_cost, left_out_between_segments, together};
 use super::region::Region;
 use super::relaxed::relaxed_value;
 use super::worst::{certifiable_from_above, worst};
@@ -210,9 +210,9 @@ fn left_out(problem: &Problem) -> Vec<String> {
         (require_free_beta(problem).is_err(), "beta that stays along the path"),
         (expected_cost(problem).is_some(), &nearest),
         (!problem.external_axes.is_empty(), "which position of the external axes goes with which x, y, z and yaw"),
-        (are_segments_apart(problem), "that all segments have the same x, y, z and yaw"),
     ];
-    all.into_iter().filter(|(is_so, _)| *is_so).map(|(_, words)| words.to_owned()).collect()
+    let of_all = all.into_iter().filter(|(is_so, _)| *is_so).map(|(_, words)| words.to_owned());
+    of_all.chain(left_out_between_segments(problem)).collect()
 }
 
 impl Certificate {
@@ -344,7 +344,8 @@ pub struct OpenBox {
     pub bound: f64,
     /// The name of the orientation of the part, where there are several.
     pub orientation: Option<String>,
-    /// The number of the segment, from 1, where segments are bounded one by one: the bound is of it alone.
+    /// The number of the segment, from 1, that stands in it, where each has a place of its own: the bound is of all
+    /// segments then, or of it alone, where the tool leans.
     pub segment: Option<usize>,
 }
 

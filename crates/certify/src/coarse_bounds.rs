@@ -12,8 +12,8 @@ use super::sliding_min::joined;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::ops::Range;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::{Monitor, Stop};
 use stead_problem::criterion::Aggregate;
@@ -22,16 +22,16 @@ use stead_problem::criterion::Aggregate;
 /// first needed.
 #[derive(Debug)]
 pub(super) struct CoarseBounds {
-    pub levels: Vec<Level>,
-    finer: Vec<FinerLevel>,
+    pub levels: Arc<[Level]>,
+    finer: Arc<[FinerLevel]>,
     /// What the parts of the finer levels made so far take. bytes
-    made: AtomicU64,
+    made: Arc<AtomicU64>,
     extent: Extent,
     steps: Steps,
     /// For each path point the number of its kind of load and how many times as large its own is; `None` where it is
     /// left out.
     kind_of: Vec<Option<(usize, f64)>>,
-    kinds: Vec<Kind>,
+    kinds: Arc<[Kind]>,
 }
 
 #[derive(Debug, Clone)]
@@ -99,7 +99,20 @@ impl CoarseBounds {
         let finest = FINER.min(model.table.depth().saturating_sub(1));
         let finer = |level| FinerLevel { level, counts: model.table.counts(level), rows: OnceLock::new() };
         let finer = (1..=finest).map(finer).collect();
-        Ok(Self { levels, finer, made: AtomicU64::new(0), extent, steps, kind_of, kinds })
+        let (levels, kinds) = (levels.into(), kinds.into());
+        Ok(Self { levels, finer, made: Arc::default(), extent, steps, kind_of, kinds })
+    }
+
+    /// The same tables for some of the path points.
+    pub fn on_points(&self, points: Range<usize>) -> Self {
+        Self {
+            levels: Arc::clone(&self.levels),
+            finer: Arc::clone(&self.finer),
+            made: Arc::clone(&self.made),
+            kinds: Arc::clone(&self.kinds),
+            kind_of: self.kind_of[points].to_vec(),
+            ..*self
+        }
     }
 
     /// The finest level whose entries answer for a box so many times as large as the coarsest steps of the table of
@@ -385,7 +398,8 @@ fn part_of_set(
             unknown |= !around.collect(level, at, cell, &mut found);
         }
         for (number, kind) in kinds.iter().enumerate() {
-            let mut of_kind = OfKind::new(&found, kind);
+            // What the coarsest level leaves open is bounded by much that takes longer.
+            let mut of_kind = OfKind::new(&found, kind, level == 0);
             for (k, direction) in directions.iter().enumerate() {
                 let below = if unknown { ZERO } else { of_kind.minorant(direction, half) };
                 out[(k * kinds.len() + number) * 4 + class.index()] = below;

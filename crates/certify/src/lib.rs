@@ -49,6 +49,7 @@
 )]
 
 mod active_cells;
+mod apart;
 mod arm;
 mod best;
 mod branch_and_bound;
@@ -74,6 +75,7 @@ mod part;
 mod region;
 mod relaxed;
 mod requirements;
+mod shared_cells;
 mod sliding_min;
 mod upper_bound;
 mod worst;
@@ -81,13 +83,13 @@ mod worst;
 #[cfg(test)]
 mod tests;
 
-pub use branch_and_bound::{Bound, Status};
+pub use branch_and_bound::{Bound, OpenIn, Status};
 pub use certificate::{
     BOUND_DECIMALS, Certificate, MAX_GAP_PERCENT, NoProof, OpenBox, Proof, Relaxation, certify, no_certificate,
 };
 pub use forecast::{Forecast, Outlook};
 pub use keeps_open::KeepsOpen;
-pub use part::{OpenIn, best, certifiable, expected_cost};
+pub use part::{best, certifiable, expected_cost};
 pub use region::Region;
 pub use relaxed::relaxed_value;
 pub use worst::worst;

@@ -252,6 +252,7 @@ struct AroundRegion {
 pub(super) struct OfKind<'a> {
     found: &'a [ModelledRegion],
     kind: &'a Kind,
+    is_sharp: bool,
     /// By how much the scores of the loads of the kind can differ from that of its own, region by region. m
     spreads: Vec<f64>,
     /// At the middle of each region (m), and slopes.
@@ -259,13 +260,14 @@ pub(super) struct OfKind<'a> {
 }
 
 /// Regions evaluated again with sharp tangents, at most.
-const SHARPENED: usize = 8;
+const SHARPENED: usize = 24;
 
 impl<'a> OfKind<'a> {
-    pub fn new(found: &'a [ModelledRegion], kind: &'a Kind) -> Self {
+    /// With tangents that are sharp in every region, or only in those that keep a bound low.
+    pub fn new(found: &'a [ModelledRegion], kind: &'a Kind, is_sharp: bool) -> Self {
         let is_spread = kind.force_spread != 0.0 || kind.moment_spread != 0.0 || kind.part_spread != 0.0;
         let of = |region: &ModelledRegion| if is_spread { region.spread(kind) } else { 0.0 };
-        Self { found, kind, spreads: found.iter().map(of).collect(), least: Vec::with_capacity(found.len()) }
+        Self { found, kind, is_sharp, spreads: found.iter().map(of).collect(), least: Vec::with_capacity(found.len()) }
     }
 
     /// Below what all of the states cost, for directions of the load within `half` of one.
@@ -279,7 +281,7 @@ impl<'a> OfKind<'a> {
         let score = |region: &ModelledRegion, is_sharp| region.least_score(load, direction, h_chi, is_sharp);
         let sharp = |region: &ModelledRegion| score(region, true);
         // Without errors of the force the one is as sharp as the other.
-        let is_above_zero = if !load.is_single() && load.error > 0.0 {
+        let is_above_zero = if !self.is_sharp && !load.is_single() && load.error > 0.0 {
             let is_above_zero = self.each(|region| score(region, false), sharp);
             if is_above_zero {
                 self.sharpen(h_chi, sharp);

@@ -7,10 +7,11 @@ use super::cost::{PointCost, Without};
 use super::load::Objective;
 use super::region::{Point, PolarModel, Region};
 use std::ops::Range;
+use std::sync::Arc;
 use stead_model::robot::Robot;
 use stead_problem::beta_step::BetaStep;
 use stead_problem::criterion::Over;
-use stead_problem::problem::Problem;
+use stead_problem::problem::{Cell, Problem};
 use stead_problem::symmetry::Upright;
 
 /// Steps of the coarsest tables, and their number.
@@ -47,8 +48,8 @@ pub(super) struct OtherSet {
 /// What is to be bounded, prepared.
 #[derive(Debug)]
 pub(super) struct Model {
-    pub arm: Arm,
-    pub table: ComplianceTable,
+    pub arm: Arc<Arm>,
+    pub table: Arc<ComplianceTable>,
     pub points: Vec<Point>,
     pub segments: Vec<Range<usize>>,
     /// Which limits on beta along the path are kept.
@@ -57,7 +58,7 @@ pub(super) struct Model {
     /// allow. rad
     pub changes: Vec<BetaStep>,
     /// The same arm with the other sets of stiffness that a score covers, where there are several.
-    pub others: Vec<OtherSet>,
+    pub others: Arc<[OtherSet]>,
     /// How the scores under the sets make up that of a point.
     pub over: Over,
     pub yaws: Yaws,
@@ -86,8 +87,8 @@ impl Model {
         };
         let points = points_of(problem);
         Self {
-            arm: arm(&robots[0]),
-            table: table(),
+            arm: Arc::new(arm(&robots[0])),
+            table: Arc::new(table()),
             keeps,
             changes: (0..points.len()).map(change).collect(),
             points,
@@ -96,6 +97,26 @@ impl Model {
             over: problem.criterion.stiffness.as_ref().map_or(Over::Mean, |sets| sets.over),
             yaws: Yaws::new(problem),
             objective: Objective::of(problem),
+        }
+    }
+
+    /// Of a problem whose cell is made of pieces.
+    pub fn of(problem: &Problem, pieces: &[Cell]) -> Self {
+        Self { yaws: Yaws::of(pieces, problem), ..Self::new(problem) }
+    }
+
+    /// The same of one of the segments alone, with the same tables.
+    pub fn on_segment(&self, segment: usize) -> Self {
+        let span = self.segments[segment].clone();
+        Self {
+            arm: Arc::clone(&self.arm),
+            table: Arc::clone(&self.table),
+            others: Arc::clone(&self.others),
+            points: self.points[span.clone()].to_vec(),
+            segments: std::iter::once(0..span.len()).collect(),
+            changes: self.changes[span].to_vec(),
+            yaws: self.yaws.clone(),
+            ..*self
         }
     }
 

@@ -1,14 +1,17 @@
 //! A problem as the parts that are bounded by themselves, and how their bounds make up one.
 
+use super::apart;
 use super::best::bound_of;
-use super::branch_and_bound::{Bound, Status};
+use super::branch_and_bound::{Bound, OpenIn, Status};
 use super::cell::{NEAREST, too_near};
 use super::load::Objective;
 use super::relaxed::low_value;
-use super::requirements::Leaf;
+use super::requirements::{Leaf, cell_moved};
+use super::shared_cells::SharedCells;
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
-use stead_model::external_axis::AxisUse;
+use stead_model::external_axis::{AxisUse, ExternalAxis};
 use stead_model::task::KeptPoint;
 use stead_numerics::monitor::Monitor;
 use stead_problem::criterion::CANCELLATION;
@@ -24,20 +27,12 @@ pub(super) enum Part {
     Leaf(Box<Leaf>),
     /// The orientations of the part by name: the least of their bounds holds.
     Least(Vec<(String, Part)>),
-    /// The segments that count, by number from 0, where external axes have another position for each: seen from
-    /// the robot no two need have the same placement, and their bounds make up the figure.
+    /// A problem whose external axes have another position for each segment, in a cell that holds all places to which
+    /// the axes at one place for the path bring the part; and the same where all axes do.
+    Apart(Box<Problem>, Box<Leaf>),
+    /// The segments that count, by number from 0, of one whose tool leans: seen from the robot no two need have the
+    /// same placement, and their bounds make up the figure.
     Sum(Objective, Vec<(usize, Leaf)>),
-}
-
-/// The open boxes of a part of a problem that is bounded by itself: of one orientation of the part, and of one segment.
-#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize)]
-pub struct OpenIn {
-    /// The name of the orientation, where there are several.
-    pub orientation: Option<String>,
-    /// The number of the segment, from 1, where segments are bounded one by one.
-    pub segment: Option<usize>,
-    /// How many boxes are open in it.
-    pub boxes: usize,
 }
 
 /// Whether the best placement of a problem can be certified with tables of at most `memory` bytes when they are empty,
@@ -88,8 +83,8 @@ pub(super) fn together(mut reasons: Vec<Unsupported>) -> Unsupported {
     if reasons.len() == 1 { reasons.swap_remove(0) } else { Unsupported::Several(reasons) }
 }
 
-/// Reasons without repetitions.
-pub(super) fn once_each(all: impl Iterator<Item = Unsupported>) -> Vec<Unsupported> {
+/// All without repetitions.
+pub(super) fn once_each<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
     all.fold(Vec::new(), |mut said, reason| {
         if !said.contains(&reason) {
             said.push(reason);
@@ -126,6 +121,11 @@ impl Part {
             return all((0..problem.orientations.len()).map(one)).map(Self::Least);
         }
         if are_segments_apart(problem) {
+            let leaf = Leaf::of(&with_axes_still(problem)?, memory)?;
+            if !leaf.leans {
+                let shared = problem.in_cell(cell_moved(problem, |axis| axis.axis_use == AxisUse::Fixed));
+                return Ok(Self::Apart(Box::new(shared), Box::new(leaf)));
+            }
             let one = |segment: usize| Ok((segment, Leaf::of(&on_segment(problem, segment)?, memory)?));
             let spans = problem.task.segments();
             let counts = |segment: &usize| spans[*segment].clone().any(|point| problem.point_weight(point) > 0.0);
@@ -137,9 +137,19 @@ impl Part {
 
     fn leaves(&self) -> Vec<&Leaf> {
         match self {
-            Self::Leaf(leaf) => vec![leaf],
+            Self::Leaf(leaf) | Self::Apart(_, leaf) => vec![leaf],
             Self::Least(parts) => parts.iter().flat_map(|(_, part)| part.leaves()).collect(),
             Self::Sum(_, parts) => parts.iter().map(|(_, leaf)| leaf).collect(),
+        }
+    }
+
+    /// What is left out of what segments share: in words.
+    fn left_out(&self) -> Vec<String> {
+        match self {
+            Self::Leaf(_) => Vec::new(),
+            Self::Least(parts) => once_each(parts.iter().flat_map(|(_, part)| part.left_out())),
+            Self::Apart(shared, leaf) => SharedCells::new(shared, &leaf.problem).left_out(),
+            Self::Sum(..) => vec!["that all segments have the same x, y, z, yaw".to_owned()],
         }
     }
 
@@ -161,6 +171,7 @@ impl Part {
                 Ok((bound, vec![OpenIn { boxes, ..OpenIn::default() }]))
             }
             Self::Least(parts) => least(parts, value, settings, monitor),
+            Self::Apart(problem, leaf) => Ok(apart::best(problem, leaf, value, settings, monitor)),
             Self::Sum(objective, parts) => sum(objective, parts, value, settings, monitor),
         }
     }
@@ -180,6 +191,33 @@ fn in_orientation(problem: &Problem, number: usize) -> Result<Problem, Vec<Unsup
 /// Whether segments are bounded one by one: external axes have another position for each.
 pub(super) fn are_segments_apart(problem: &Problem) -> bool {
     problem.task.segments().len() > 1 && problem.external_axes.iter().any(|axis| axis.axis_use == AxisUse::Indexed)
+}
+
+/// What a bound of a problem leaves out of what its segments share: in words.
+pub(super) fn left_out_between_segments(problem: &Problem) -> Vec<String> {
+    if !are_segments_apart(problem) {
+        return Vec::new();
+    }
+    let mut said = Part::of(problem, u64::MAX).map_or_else(|_| Vec::new(), |part| part.left_out());
+    let counts = |span: &Range<usize>| span.clone().any(|point| problem.point_weight(point) > 0.0);
+    if !problem.task.segments().iter().all(counts) {
+        said.push("segments without scored points".to_owned());
+    }
+    said
+}
+
+/// The same problem with each external axis at one place for the path.
+fn with_axes_still(problem: &Problem) -> Result<Problem, Vec<Unsupported>> {
+    let changed = problem.changed(|parts| {
+        let still = |axis: &ExternalAxis| match axis.axis_use {
+            AxisUse::Indexed => ExternalAxis { axis_use: AxisUse::Fixed, ..axis.clone() },
+            AxisUse::Fixed | AxisUse::Continuous => axis.clone(),
+        };
+        parts.external_axes = parts.external_axes.iter().map(still).collect();
+        (parts.scene, parts.setup) =
+            (None, Setup { leans: parts.setup.leans.clone(), ..Setup::at_rest(&parts.external_axes) });
+    });
+    changed.map_err(|_| vec![Unsupported::OtherAxes])
 }
 
 /// The same problem on one segment (from 0) alone.
@@ -293,4 +331,4 @@ fn first_of(a: Status, b: Status) -> Status {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -21,6 +21,8 @@ use stead_problem::symmetry::{Unsupported, Upright, is_vertical, require_constan
 pub(super) struct Leaf {
     /// With external axes as a larger cell.
     pub problem: Problem,
+    /// What that cell is made of: of arcs that turntables bring the part along.
+    pub pieces: Vec<Cell>,
     /// Whether the tool leans at some point of the path.
     pub leans: bool,
 }
@@ -51,7 +53,9 @@ impl Leaf {
             reasons.extend((bytes > memory).then_some(Unsupported::TooLarge { bytes, max: memory }));
         }
         match (alone, axes) {
-            (Ok(alone), Ok(axes)) if reasons.is_empty() => Ok(Self { problem: alone.into_owned(), leans: axes > 0 }),
+            (Ok(alone), Ok(axes)) if reasons.is_empty() => {
+                Ok(Self { pieces: pieces(problem), problem: alone.into_owned(), leans: axes > 0 })
+            }
             _ => Err(reasons),
         }
     }
@@ -142,12 +146,7 @@ pub(super) fn without_axes(problem: &Problem) -> Result<Cow<'_, Problem>, Unsupp
     if !axes.iter().all(is_covered) {
         return Err(Unsupported::OtherAxes);
     }
-    // What is carried by several axes is moved by the last one first; a robot that moves one way is a workpiece that
-    // moves the other way, and there the first axis moves it first.
-    let carrying = |what: Carried| axes.iter().filter(move |axis| axis.carries == what);
-    let workpiece = carrying(Carried::Workpiece).rev().map(|axis| (axis, 1.0));
-    let robot = carrying(Carried::Robot).map(|axis| (axis, -1.0));
-    let cell = workpiece.chain(robot).fold(problem.cell, |cell, (axis, sign)| moved(cell, axis, sign));
+    let cell = cell_moved(problem, |_| true);
     let alone = problem.changed(|parts| {
         (parts.external_axes, parts.scene, parts.cell) = (Vec::new(), None, cell);
         parts.setup = Setup { positions: Default::default(), ..parts.setup.clone() };
@@ -155,19 +154,59 @@ pub(super) fn without_axes(problem: &Problem) -> Result<Cow<'_, Problem>, Unsupp
     alone.map(Cow::Owned).map_err(|_| Unsupported::OtherAxes)
 }
 
-/// A cell that holds all places to which an axis brings those of a cell, moving it by `sign` times its positions.
-fn moved(cell: Cell, axis: &ExternalAxis, sign: f64) -> Cell {
+/// A cell that holds all places to which some of the external axes bring those of the cell of a problem.
+pub(super) fn cell_moved(problem: &Problem, by: impl Fn(&ExternalAxis) -> bool) -> Cell {
+    moving(problem)
+        .filter(|(axis, _)| by(axis))
+        .fold(problem.cell, |cell, (axis, sign)| moved(cell, axis, sign, Interval { min: axis.min, max: axis.max }))
+}
+
+/// The external axes in the order in which they move the workpiece against the robot, with the sign of their motion.
+///
+/// What is carried by several axes is moved by the last one first; a robot that moves one way is a workpiece that moves
+/// the other way, and there the first axis moves it first.
+fn moving(problem: &Problem) -> impl Iterator<Item = (&ExternalAxis, f64)> {
+    let carrying = |what: Carried| problem.external_axes.iter().filter(move |axis| axis.carries == what);
+    let workpiece = carrying(Carried::Workpiece).rev().map(|axis| (axis, 1.0));
+    workpiece.chain(carrying(Carried::Robot).map(|axis| (axis, -1.0)))
+}
+
+/// Cells that together hold all places to which the external axes bring those of the cell of a problem: turntables in
+/// arcs, each with its own yaws. One cell where these would be too many.
+fn pieces(problem: &Problem) -> Vec<Cell> {
+    let arcs = |axis: &ExternalAxis| match axis.kind {
+        AxisKind::Rail => 1,
+        AxisKind::Turntable => ((axis.max - axis.min) / ARC).ceil().clamp(1.0, MOST_PIECES as f64) as usize,
+    };
+    if moving(problem).map(|(axis, _)| arcs(axis)).fold(1, usize::saturating_mul) > MOST_PIECES {
+        return vec![cell_moved(problem, |_| true)];
+    }
+    moving(problem).fold(vec![problem.cell], |cells, (axis, sign)| {
+        let (count, width) = (arcs(axis), axis.max - axis.min);
+        let at = |k: usize| axis.min + width * k as f64 / count as f64;
+        let arc = |k: usize| Interval { min: at(k), max: at(k + 1) };
+        cells.iter().flat_map(|cell| (0..count).map(move |k| moved(*cell, axis, sign, arc(k)))).collect()
+    })
+}
+
+/// Arcs of turntables are no longer than this (rad), and pieces of a cell no more.
+const ARC: f64 = 5.0 * PI / 180.0;
+const MOST_PIECES: usize = 400;
+
+/// A cell that holds all places to which a range of positions of an axis brings those of a cell, moving it by `sign`
+/// times these.
+fn moved(cell: Cell, axis: &ExternalAxis, sign: f64, range: Interval) -> Cell {
     let Cell { mut position, mut yaw } = cell;
     if axis.kind == AxisKind::Rail {
-        let ends: [Vector3<f64>; 2] = [axis.min, axis.max].map(|at| axis.direction * (sign * at));
-        for (k, range) in position.iter_mut().enumerate() {
+        let ends: [Vector3<f64>; 2] = [range.min, range.max].map(|at| axis.direction * (sign * at));
+        for (k, place) in position.iter_mut().enumerate() {
             let (a, b) = (ends[0][k], ends[1][k]);
-            *range = Interval { min: range.min + a.min(b), max: range.max + a.max(b) };
+            *place = Interval { min: place.min + a.min(b), max: place.max + a.max(b) };
         }
         return Cell { position, yaw };
     }
     let sign = sign * axis.direction.z.signum();
-    let (a, b) = (sign * axis.min, sign * axis.max);
+    let (a, b) = (sign * range.min, sign * range.max);
     let turn = Interval { min: a.min(b), max: a.max(b) };
     // At each angle the corners are the farthest.
     let [x, y, _] = position;
@@ -194,7 +233,7 @@ fn moved(cell: Cell, axis: &ExternalAxis, sign: f64) -> Cell {
 const ROUNDING: f64 = 1e-12;
 
 /// The least and the largest of `radius` times the cosine of angles from `from` to `to` (rad).
-fn farthest(radius: f64, from: f64, to: f64) -> Interval {
+pub(super) fn farthest(radius: f64, from: f64, to: f64) -> Interval {
     let has = |angle: f64| angle + TAU * ((from - angle) / TAU).ceil() <= to;
     let [a, b] = [from, to].map(|angle| radius * libm::cos(angle));
     Interval { min: if has(PI) { -radius } else { a.min(b) }, max: if has(0.0) { radius } else { a.max(b) } }

@@ -148,7 +148,7 @@ fn placement_in(problem: &Problem, region: &Region) -> Placement {
 fn without_rate(problem: &Problem) -> Model {
     let model = Model::new(problem);
     let (extent, _) = model.table.grid();
-    Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model }
+    Model { table: ComplianceTable::new(extent, STEPS, LEVELS).into(), ..model }
 }
 
 /// The boxes to begin with, together all of the cell; larger ones once the caller asks to stop.

@@ -33,7 +33,7 @@ use std::sync::Arc;
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::Monitor;
 use stead_problem::criterion::Aggregate;
-use stead_problem::problem::Problem;
+use stead_problem::problem::{Cell, Problem};
 use stead_problem::sense::Sense;
 use stead_problem::settings::CertificateSettings;
 
@@ -71,13 +71,19 @@ type Classes = Option<Arc<[u8]>>;
 /// A box of placements: x, y and height of the workpiece origin about axis 1, in the directions of the workpiece.
 type Box3 = Region;
 
-/// Bounds the objective of all placements of a problem from below: see [`super::best()`].
-pub(super) fn best(problem: &Problem, value: f64, settings: &CertificateSettings, monitor: &Monitor) -> Bound {
+/// Bounds the objective of all placements of a problem from below, whose cell is made of pieces: see [`super::best()`].
+pub(super) fn best(
+    problem: &Problem,
+    pieces: &[Cell],
+    value: f64,
+    settings: &CertificateSettings,
+    monitor: &Monitor,
+) -> Bound {
     let CertificateSettings { gap, memory, .. } = *settings;
     let objective = Objective::of(problem);
     let search = BranchAndBound { sense: Sense::Min, value, gap, keeps: Keeps::NOTHING, objective, memory };
     let ceiling = search.ceiling();
-    let model = Leaning::new(problem, ceiling);
+    let model = Leaning { yaws: Yaws::of(pieces, problem), ..Leaning::new(problem, ceiling) };
     let start = model.start(&whole(problem)).into_iter();
     let all = Parts {
         start: start.map(|region| Open { bound: 0.0, region, known: None }).collect(),

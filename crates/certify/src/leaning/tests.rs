@@ -303,7 +303,7 @@ fn an_optimum_planted_in_a_small_cell_is_not_passed() {
         }
         tried += 1;
         let settings = CertificateSettings::new(0.01);
-        let bound = best(&problem, least, &settings, &monitor);
+        let bound = crate::best(&problem, least, &settings, &monitor).unwrap();
         assert!(bound.bound <= least && bound.bound > 0.98 * least, "{yaw}: {} {least}", bound.bound);
     }
     assert!(tried > 1);
@@ -315,7 +315,8 @@ fn what_keeps_boxes_open_is_counted() {
     problem.criterion.weights = Weights::TOTAL;
     problem.constraints.min_inverse_condition = 0.3;
     let until = std::time::Instant::now() + std::time::Duration::from_secs(4);
-    let bound = best(&problem, 1e-4, &CertificateSettings::new(0.001), &Monitor::silent().with_deadline(Some(until)));
+    let monitor = Monitor::silent().with_deadline(Some(until));
+    let bound = crate::best(&problem, 1e-4, &CertificateSettings::new(0.001), &monitor).unwrap();
     assert_eq!(bound.status, Status::TimeLimit);
     let KeepsOpen { states, unknown, undecided, by, .. } = bound.keeps_open.unwrap();
     assert!(undecided > 0 && unknown + undecided <= states, "{:?}", bound.keeps_open);

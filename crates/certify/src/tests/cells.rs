@@ -38,7 +38,7 @@ fn left_out(settings: &mut [Setting], change: fn(&mut Setting)) -> usize {
     let mut wrong = 0;
     for setting in settings {
         let whole = setting.whole;
-        let yaws = setting.model.yaws;
+        let yaws = setting.model.yaws.clone();
         change(setting);
         for _ in 0..60 {
             let at = coordinates(setting, &pose_in(&setting.problem, &mut random));
@@ -62,13 +62,13 @@ fn cells_are_in_their_boxes_and_broken_boxes_are_seen() {
     let mut around = five_segments();
     around.cell.position[1] = Interval { min: -0.2, max: 0.4 };
     settings.push(Setting::new(around));
-    assert!(settings.iter().filter(|s| s.model.yaws.range.is_some()).count() >= 30);
+    assert!(settings.iter().filter(|s| s.model.yaws.0[0].range.is_some()).count() >= 30);
     assert_eq!(left_out(&mut settings, |_| {}), 0);
     let mutations: [Breaking<Setting>; 6] = [
-        ("yaws turned the other way", |s| s.model.yaws.range = s.model.yaws.range.map(|(m, h)| (-m, h))),
+        ("yaws turned the other way", |s| s.model.yaws.0[0].range = s.model.yaws.0[0].range.map(|(m, h)| (-m, h))),
         ("yaws without the azimuths of the cell", |s| {
             let half = s.problem.cell.yaw.width() / 2.0;
-            s.model.yaws.range = s.model.yaws.range.map(|(m, _)| (m, half));
+            s.model.yaws.0[0].range = s.model.yaws.0[0].range.map(|(m, _)| (m, half));
         }),
         ("height upside down", |s| s.whole.middle[1] = -s.whole.middle[1]),
         ("height a hundredth lower", |s| s.whole.half[1] *= 0.99),

@@ -18,14 +18,14 @@ pub fn local(setting: &Setting, radius: (f64, f64), height: (f64, f64), steps: S
     let b = &setting.model;
     Model {
         arm: b.arm.clone(),
-        table: ComplianceTable::new(Extent { radius, height }, steps, levels),
+        table: ComplianceTable::new(Extent { radius, height }, steps, levels).into(),
         points: b.points.clone(),
         segments: b.segments.clone(),
         keeps: b.keeps,
         changes: b.changes.clone(),
-        others: Vec::new(),
+        others: [].into(),
         over: b.over,
-        yaws: b.yaws,
+        yaws: b.yaws.clone(),
         objective: b.objective,
     }
 }
@@ -110,7 +110,7 @@ pub fn violations(setting: &Setting, steps: Steps, mutation: &Mutation) -> [usiz
         let direction = Direction::new(place[2] + load.turn);
         // The load of another point stands for it, as coarse tables have kinds of load.
         let (kind, size) = kind_of(&model, point, mutation.spread);
-        let mut e = OfKind::new(&found, &kind).minorant(&direction, half);
+        let mut e = OfKind::new(&found, &kind, random.random()).minorant(&direction, half);
         e.value *= size;
         e.slope = e.slope.map(|slope| slope * size);
         if e == ZERO {
@@ -225,7 +225,7 @@ fn regions_cut_up_are_below_the_cost_too() {
         let load = &model.points[point].load;
         let direction = Direction::new(place[2] + load.turn);
         let kind = Kind { load: *load, force_spread: 0.0, moment_spread: 0.0, part_spread: 0.0 };
-        let e = OfKind::new(&found, &kind).minorant(&direction, half);
+        let e = OfKind::new(&found, &kind, random.random()).minorant(&direction, half);
         for _ in 0..6 {
             let s = shares(&mut random);
             let off = [s[0] * COARSE.length, s[1] * COARSE.length, s[2] * turn];

@@ -72,16 +72,13 @@ impl Setting {
     /// Takes the tables of another setting, which are what takes long to make, where they are of the same arm.
     pub fn take_table(&mut self, other: Option<Self>) {
         let Some(other) = other else { return };
-        let take = |(arm, table): (&Arm, &mut ComplianceTable), (its, theirs): (&Arm, ComplianceTable)| {
-            let of = |arm: &Arm, table: &ComplianceTable| format!("{arm:?} {:?}", table.grid());
-            if of(arm, table) == of(its, &theirs) {
-                *table = theirs;
-            }
+        let of = |arm: &Arm, table: &ComplianceTable| format!("{arm:?} {:?}", table.grid());
+        let all = |model: &Model| {
+            let others = model.others.iter().map(|set| of(&set.arm, &set.table));
+            std::iter::once(of(&model.arm, &model.table)).chain(others).collect::<Vec<_>>()
         };
-        let (mine, theirs) = (&mut self.model, other.model);
-        take((&mine.arm, &mut mine.table), (&theirs.arm, theirs.table));
-        for (mine, theirs) in mine.others.iter_mut().zip(theirs.others) {
-            take((&mine.arm, &mut mine.table), (&theirs.arm, theirs.table));
+        if all(&self.model) == all(&other.model) {
+            (self.model.table, self.model.others) = (other.model.table, other.model.others);
         }
     }
 

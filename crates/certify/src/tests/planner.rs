@@ -6,6 +6,7 @@ use super::super::sliding_min::{INFINITE, SlidingMin, min_into};
 use super::minorants::local;
 use super::*;
 use crate::compliance_table::Steps;
+use std::sync::Arc;
 use stead_model::task::{PathPoint, ToolPath};
 use stead_model::testing::some;
 use stead_numerics::monitor::Monitor;
@@ -187,7 +188,7 @@ fn a_broken_sum_is_seen() {
         ("forces a tenth larger", |setting| {
             setting.model.points.iter_mut().for_each(|p| p.load.force = p.load.force.map(|f| 1.1 * f));
         }),
-        ("joint 1 twice", |setting| setting.model.arm.joint1 *= 2.0),
+        ("joint 1 twice", |setting| Arc::make_mut(&mut setting.model.arm).joint1 *= 2.0),
     ];
     let mut last = None;
     for (name, change) in mutations {
