@@ -232,6 +232,8 @@ impl Apart {
             let known: Vec<(usize, Known)> = held.into_iter().map(|held| (held.segment, held.open.known)).collect();
             bound.keeps_open = KeepsOpen::of(&bound.open, &known, |counted, region, (segment, known)| {
                 count_box(&self.segments[*segment].model, counted, region, known, value);
+                // Of one segment they say nothing of the value.
+                counted.sums = None;
                 counted.seconds = Some(self.spent.seconds()).filter(|_| bound.status == Status::TimeLimit);
             });
         }
