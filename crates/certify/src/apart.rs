@@ -5,11 +5,12 @@
 //! the boxes of that segment that reach it. A box is open as long as its own bound and what the other segments cost in
 //! one of the cells that it reaches come to less than the ceiling.
 
-use super::best::{CELLS, Known, Spent, TABLES, count_box, parts};
+use super::best::{Known, Spent, TABLES, count_box, parts};
 use super::branch_and_bound::{BATCH, Bound, BranchAndBound, Open, OpenIn, Status, widest};
 use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
 use super::keeps_open::KeepsOpen;
+use super::load::Objective;
 use super::model::Model;
 use super::region::Region;
 use super::requirements::Leaf;
@@ -44,7 +45,7 @@ struct HeldBox {
 struct Apart {
     segments: Vec<Segment>,
     cells: SharedCells,
-    aggregate: Aggregate,
+    objective: Objective,
     /// What the points have to cost together for a placement to be of interest.
     ceiling: f64,
     spent: Spent,
@@ -85,7 +86,7 @@ pub(super) fn best(
     };
     let segments: Vec<Segment> = (0..model.segments.len()).filter(counts).map(segment).collect();
     let cells = SharedCells::new(problem, widened);
-    let apart = Apart { segments, cells, aggregate: objective.aggregate, ceiling: search.ceiling(), spent };
+    let apart = Apart { segments, cells, objective, ceiling: search.ceiling(), spent };
     let mut held = apart.start(whole);
     let mut nodes = held.len();
     let (status, bound) = loop {
@@ -139,13 +140,14 @@ impl Apart {
     /// Segment by segment, and cell by cell, of which there are so many: what the others cost together, of what each
     /// costs at least.
     fn others(&self, least: &[f64], count: usize) -> Vec<f64> {
+        let aggregate = self.objective.aggregate;
         let mut others = vec![0.0; least.len()];
         let (mut before, mut after) = (vec![0.0; count], vec![0.0; count]);
         let mut add = |place: usize, sums: &mut [f64]| {
             for (cell, sum) in sums.iter_mut().enumerate() {
                 let at = place * count + cell;
-                others[at] = self.aggregate.join(others[at], *sum);
-                *sum = self.aggregate.join(*sum, least[at]);
+                others[at] = aggregate.join(others[at], *sum);
+                *sum = aggregate.join(*sum, least[at]);
             }
         };
         (0..self.segments.len()).for_each(|place| add(place, &mut before));
@@ -155,7 +157,7 @@ impl Apart {
 
     /// What all segments cost together where a box reaches, at least.
     fn come_to(&self, held: &HeldBox) -> f64 {
-        self.aggregate.join(held.open.bound, held.others)
+        self.objective.aggregate.join(held.open.bound, held.others)
     }
 
     /// Boxes of the least are cut first: what all segments cost together where it reaches, less what its own bound may
@@ -201,15 +203,11 @@ impl Apart {
             return None;
         }
         let Segment { model, coarse, .. } = &self.segments[held.segment];
-        let most = match self.aggregate {
+        let most = match self.objective.aggregate {
             Aggregate::Mean | Aggregate::Rms => self.ceiling - held.others,
             Aggregate::Max => self.ceiling,
         };
-        let since = Instant::now();
-        let parts = parts(model, coarse, &held.open, most, monitor);
-        let is_by_cells = parts.iter().flatten().any(|part| part.known.is_some());
-        self.spent.add(if is_by_cells { CELLS } else { TABLES }, 1, since);
-        parts
+        self.spent.on_parts(|| parts(model, coarse, &held.open, most, monitor))
     }
 
     /// The bound that `ended` makes of the boxes that are left, and how many are of each segment.
@@ -225,9 +223,8 @@ impl Apart {
             OpenIn { segment: Some(segment.number + 1), boxes, ..OpenIn::default() }
         };
         let open_in = self.segments.iter().enumerate().map(of).collect();
-        let objective = self.segments.first().map(|segment| segment.model.objective);
-        let come_to = |held: &HeldBox| objective.map_or(0.0, |objective| objective.value(self.come_to(held)));
-        let mut bound = ended(held.iter().map(|held| (held.open.region, come_to(held))).collect());
+        let come_to = |held: &HeldBox| (held.open.region, self.objective.value(self.come_to(held)));
+        let mut bound = ended(held.iter().map(come_to).collect());
         if !matches!(bound.status, Status::Reached | Status::Interrupted) {
             let known: Vec<(usize, Known)> = held.into_iter().map(|held| (held.segment, held.open.known)).collect();
             bound.keeps_open = KeepsOpen::of(&bound.open, &known, |counted, region, (segment, known)| {

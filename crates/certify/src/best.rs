@@ -56,14 +56,7 @@ fn upright(leaf: &Leaf, value: f64, settings: &CertificateSettings, monitor: &Mo
     let all = Parts {
         start,
         nodes,
-        of: |open: &Open<Known>| {
-            let since = Instant::now();
-            let parts = parts(&model, &coarse, open, ceiling, monitor);
-            // A box of which no cells were known may be bounded by them now.
-            let is_by_cells = parts.iter().flatten().any(|part| part.known.is_some());
-            spent.add(if is_by_cells { CELLS } else { TABLES }, 1, since);
-            parts
-        },
+        of: |open: &Open<Known>| spent.on_parts(|| parts(&model, &coarse, open, ceiling, monitor)),
         used: || model.used() + coarse.used(),
         bytes: |active: &Known| active.as_ref().map_or(0, |active| active.bytes()),
         count: |counted: &mut KeepsOpen, region: &Region, known: &Known| {
@@ -101,12 +94,22 @@ pub(super) struct Spent([AtomicU64; 2]);
 /// Coarse tables with their finer levels.
 pub(super) const TABLES: usize = 0;
 /// Cells of heading.
-pub(super) const CELLS: usize = 1;
+const CELLS: usize = 1;
 
 impl Spent {
     /// Adds the time of so many threads.
     pub fn add(&self, part: usize, threads: u64, since: Instant) {
         self.0[part].fetch_add(threads * since.elapsed().as_nanos() as u64, Ordering::Relaxed);
+    }
+
+    /// Adds the time that the parts of a box take.
+    pub fn on_parts(&self, parts: impl FnOnce() -> Option<Vec<Open<Known>>>) -> Option<Vec<Open<Known>>> {
+        let since = Instant::now();
+        let parts = parts();
+        // A box of which no cells were known may be bounded by them now.
+        let is_by_cells = parts.iter().flatten().any(|part| part.known.is_some());
+        self.add(if is_by_cells { CELLS } else { TABLES }, 1, since);
+        parts
     }
 
     /// s

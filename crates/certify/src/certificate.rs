@@ -344,7 +344,7 @@ pub struct OpenBox {
     pub bound: f64,
     /// The name of the orientation of the part, where there are several.
     pub orientation: Option<String>,
-    /// The number of the segment, from 1, that stands in it, where each has a place of its own: the bound is of all
+    /// The number of the segment, from 1, that it is of, where each has a place of its own: the bound is of all
     /// segments then, or of it alone, where the tool leans.
     pub segment: Option<usize>,
 }

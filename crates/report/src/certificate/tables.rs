@@ -32,7 +32,7 @@ records! {
             Some(MmDeflection(proof.rounded_mm(open.bound))).filter(|bound| bound.0.is_finite()),
         /// Name of the orientation of the part; empty where the run has one alone.
         orientation: Option<String> = open.orientation.clone(),
-        /// Number of the segment that stands in it, where each has a place of its own; else empty.
+        /// Number of the segment that it is of, where each has a place of its own; else empty.
         segment: Option<usize> = open.segment,
     }
 }
